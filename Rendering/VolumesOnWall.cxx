@@ -185,13 +185,13 @@ std::shared_ptr<const FloatImage> VolumesOnWall::Cast(const std::vector<VolumeFr
       [&] { mine = group.front()->CastOnWall(this->Renderer, wall, depths, volumes); });
     return mine;
   }
-  const auto castBand = [&](std::size_t volume, const PixelRect& band, SegmentPicture& segments)
+  const auto castBlock = [&](std::size_t volume, const PixelRect& block, SegmentPicture& segments)
   {
     float limit = 1.0f;
     const auto cast = [&]
     {
       limit =
-        group[volume]->CastSegmentsOnWall(this->Renderer, wall, depths, volumes, band, segments);
+        group[volume]->CastSegmentsOnWall(this->Renderer, wall, depths, volumes, block, segments);
     };
     if (!attempt(*group[volume], cast))
     {
@@ -205,8 +205,8 @@ std::shared_ptr<const FloatImage> VolumesOnWall::Cast(const std::vector<VolumeFr
   took.Picture = wall.Number;
   for (const PicturePlace& place : wall.Places)
   {
-    std::shared_ptr<const FloatImage> picture = MixInBands(*this->Called->State->Communicator,
-      group.size(), place.Rect, place.Root, ThreadPool::Process(), castBand, took.Sent);
+    std::shared_ptr<const FloatImage> picture = MixInBlocks(*this->Called->State->Communicator,
+      group.size(), place.Rect, place.Root, ThreadPool::Process(), castBlock, took.Sent);
     mine = picture ? std::move(picture) : std::move(mine);
   }
   took.Seconds =

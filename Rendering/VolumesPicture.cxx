@@ -346,11 +346,11 @@ std::shared_ptr<const FloatImage> VolumesPicture::Mix(const std::vector<int>& gr
   took.Volumes = static_cast<int>(this->Frames.size());
   const bool hasSurfaces = this->MixesSurfaces && CanMix(this->FrameAt(group.front()));
   const std::size_t count = group.size() + (hasSurfaces ? 1 : 0);
-  const auto castBand = [&](std::size_t volume, const PixelRect& band, SegmentPicture& segments)
+  const auto castBlock = [&](std::size_t volume, const PixelRect& block, SegmentPicture& segments)
   {
     if (volume == group.size())
     {
-      this->Surfaces.AddTo(segments, band);
+      this->Surfaces.AddTo(segments, block);
       return LeastLight;
     }
     VolumeFrame& frame = this->FrameAt(group[volume]);
@@ -358,7 +358,7 @@ std::shared_ptr<const FloatImage> VolumesPicture::Mix(const std::vector<int>& gr
     const auto cast = [&]
     {
       limit =
-        frame.CastSegments(this->Renderer, backdrop, this->TogetherWith(frame), band, segments);
+        frame.CastSegments(this->Renderer, backdrop, this->TogetherWith(frame), block, segments);
     };
     if (!this->Attempt(frame, cast, failed))
     {
@@ -366,8 +366,8 @@ std::shared_ptr<const FloatImage> VolumesPicture::Mix(const std::vector<int>& gr
     }
     return limit;
   };
-  std::shared_ptr<const FloatImage> picture = MixInBands(*this->Called->State->Communicator, count,
-    rect, /*root=*/0, ThreadPool::Process(), castBand, took.Sent);
+  std::shared_ptr<const FloatImage> picture = MixInBlocks(*this->Called->State->Communicator, count,
+    rect, /*root=*/0, ThreadPool::Process(), castBlock, took.Sent);
   took.Seconds = timer.Seconds() / static_cast<double>(group.size());
   for (const int number : group)
   {

@@ -413,13 +413,17 @@ void SurfaceLayers::Place(const PictureView& view, const PixelRect& rect, const 
   this->Fragments = {};
 }
 
-void SurfaceLayers::AddTo(SegmentPicture& segments, const PixelRect& band) const
+void SurfaceLayers::AddTo(SegmentPicture& segments, const PixelRect& block) const
 {
-  const int end = (band.Hi.y + RayTile::Edge - 1) / RayTile::Edge;
+  const int end = (block.Hi.y + RayTile::Edge - 1) / RayTile::Edge;
   const auto last = this->Tiles.lower_bound({ end, 0 });
-  for (auto at = this->Tiles.lower_bound({ band.Lo.y / RayTile::Edge, 0 }); at != last; ++at)
+  for (auto at = this->Tiles.lower_bound({ block.Lo.y / RayTile::Edge, 0 }); at != last; ++at)
   {
-    segments.Add(at->second);
+    const int low = at->second.Position.x * RayTile::Edge;
+    if (low < block.Hi.x && low + RayTile::Edge > block.Lo.x)
+    {
+      segments.Add(at->second);
+    }
   }
 }
 

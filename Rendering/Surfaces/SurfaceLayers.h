@@ -53,8 +53,8 @@ public:
   /// Finds where they are along rays, and leaves out what is behind opaque geometry of any rank.
   void Place(const PictureView& view, const PixelRect& rect, const Backdrop& backdrop);
 
-  /// Adds what is in a band of the picture, which consists of whole tiles.
-  void AddTo(SegmentPicture& segments, const PixelRect& band) const;
+  /// Adds what is in a block of the picture, which consists of whole tiles.
+  void AddTo(SegmentPicture& segments, const PixelRect& block) const;
 
 private:
   std::vector<SurfaceFragment> Fragments;

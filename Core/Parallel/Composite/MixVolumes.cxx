@@ -22,8 +22,12 @@ namespace banyan
 namespace
 {
 
-/// That segments of a band may take on a rank.
-constexpr double BandBytes = 32e6;
+/// That segments of a block may take on a rank.
+constexpr double BlockBytes = 16e6;
+/// Of segments, in what was not drawn yet.
+constexpr double LeastPerPixel = 512.0;
+/// Of the first block, of which nothing is known.
+constexpr double FirstPixels = 2.0 * RayTile::Edge * RayTile::Edge;
 
 static_assert(std::is_trivially_copyable_v<RaySegment>, "sent as it is");
 
@@ -135,6 +139,23 @@ void MixTiles(const MixedVolumes& space, ThreadPool& pool, TilePicture& picture)
   pool.ParallelFor(static_cast<std::int64_t>(tiles.size()), mix);
 }
 
+/// The next block of a picture: rows of tiles, or a part of one. Tiles are whole.
+/// @param at its lower left corner
+/// @param pixels about as many as it may have; one tile at least
+PixelRect BlockAt(const glm::ivec2& at, const PixelRect& rect, double pixels)
+{
+  constexpr int edge = RayTile::Edge;
+  const auto along = [&](double length, int from, int end)
+  {
+    const int tiles = std::max(1, static_cast<int>(std::min(length, 65536.0)) / edge);
+    return std::min((from / edge + tiles) * edge, end);
+  };
+  const int width = rect.Size().x;
+  const bool isRow = at.x == rect.Lo.x && pixels >= static_cast<double>(width) * edge;
+  return { at, { isRow ? rect.Hi.x : along(pixels / edge, at.x, rect.Hi.x),
+                 along(isRow ? pixels / width : edge, at.y, rect.Hi.y) } };
+}
+
 } // namespace
 
 FloatImage MixVolumes(Communicator& communicator, MixedVolumes space, ThreadPool& pool, int root,
@@ -151,8 +172,8 @@ FloatImage MixVolumes(Communicator& communicator, MixedVolumes space, ThreadPool
   return picture.Gather(communicator, root, failure, sent);
 }
 
-std::shared_ptr<const FloatImage> MixInBands(Communicator& communicator, std::size_t volumes,
-  const PixelRect& rect, int root, ThreadPool& pool, const CastBand& cast, SentBytes& sent)
+std::shared_ptr<const FloatImage> MixInBlocks(Communicator& communicator, std::size_t volumes,
+  const PixelRect& rect, int root, ThreadPool& pool, const CastBlock& cast, SentBytes& sent)
 {
   std::shared_ptr<FloatImage> picture;
   if (communicator.Rank() == root)
@@ -160,15 +181,14 @@ std::shared_ptr<const FloatImage> MixInBands(Communicator& communicator, std::si
     picture = std::make_shared<FloatImage>(
       FloatImage{ rect, PixelVector(static_cast<std::size_t>(rect.Count()), glm::vec4(0.0f)) });
   }
-  int rows = RayTile::Edge;
-  for (int low = rect.Lo.y; low < rect.Hi.y;)
+  double perPixel = LeastPerPixel;
+  double pixels = FirstPixels;
+  for (glm::ivec2 at = rect.Lo; at.y < rect.Hi.y;)
   {
-    // Tiles are whole.
-    const int high = std::min(low / RayTile::Edge * RayTile::Edge + rows, rect.Hi.y);
     MixedVolumes mixed;
-    mixed.Viewport = { { rect.Lo.x, low }, { rect.Hi.x, high } };
+    mixed.Viewport = BlockAt(at, rect, pixels);
     mixed.TransmittanceLimit = 1.0f;
-    double bytes = 1.0;
+    double bytes = 0.0;
     for (std::size_t volume = 0; volume < volumes; ++volume)
     {
       SegmentPicture segments;
@@ -177,16 +197,17 @@ std::shared_ptr<const FloatImage> MixInBands(Communicator& communicator, std::si
       bytes += static_cast<double>(segments.Bytes());
       mixed.Segments.push_back(segments.Take());
     }
-    const FloatImage band = MixVolumes(communicator, std::move(mixed), pool, root, {}, sent);
-    for (int y = low; y < high && picture; ++y)
+    const PixelRect block = mixed.Viewport;
+    const FloatImage drawn = MixVolumes(communicator, std::move(mixed), pool, root, {}, sent);
+    for (int y = block.Lo.y; y < block.Hi.y && picture; ++y)
     {
-      std::copy_n(&band.At(rect.Lo.x, y), rect.Size().x, &picture->At(rect.Lo.x, y));
+      std::copy_n(&drawn.At(block.Lo.x, y), block.Size().x, &picture->At(block.Lo.x, y));
     }
-    // The next band may have more.
-    const double fits = BandBytes / AllMax(communicator, bytes) * (high - low);
-    rows = static_cast<int>(std::min(fits, 4.0 * rows)) / RayTile::Edge * RayTile::Edge;
-    rows = std::max(rows, RayTile::Edge);
-    low = high;
+    // The densest block tells how large others may be.
+    perPixel = std::max(perPixel, AllMax(communicator, bytes) / static_cast<double>(block.Count()));
+    pixels = std::min(BlockBytes / perPixel, 4.0 * pixels);
+    const bool ended = block.Hi.x == rect.Hi.x;
+    at = ended ? glm::ivec2(rect.Lo.x, block.Hi.y) : glm::ivec2(block.Hi.x, at.y);
   }
   return picture;
 }

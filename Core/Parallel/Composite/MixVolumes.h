@@ -37,18 +37,18 @@ struct MixedVolumes
 FloatImage MixVolumes(Communicator& communicator, MixedVolumes space, ThreadPool& pool, int root,
   std::string failure, SentBytes& sent);
 
-/// Takes what a volume has along the rays of a band of a picture. Collective.
+/// Takes what a volume has along the rays of a block of a picture. Collective.
 /// @return the transmittance at which its rays end; 1 where it could not be drawn
-using CastBand =
-  std::function<float(std::size_t volume, const PixelRect& band, SegmentPicture& segments)>;
+using CastBlock =
+  std::function<float(std::size_t volume, const PixelRect& block, SegmentPicture& segments)>;
 
-/// Collective: the same of a picture, band after band, since segments take much memory: at most
-/// about 32 MB on a rank, or what a row of tiles has.
+/// Collective: the same of a picture, block after block, since segments take much memory: about 16
+/// MB on a rank. A block is rows of tiles, a part of one, or a tile where that alone has more.
 /// @param volumes how many there are
 /// @param sent this rank's bytes are added
 /// @return the picture on the root; null on other ranks
-std::shared_ptr<const FloatImage> MixInBands(Communicator& communicator, std::size_t volumes,
-  const PixelRect& rect, int root, ThreadPool& pool, const CastBand& cast, SentBytes& sent);
+std::shared_ptr<const FloatImage> MixInBlocks(Communicator& communicator, std::size_t volumes,
+  const PixelRect& rect, int root, ThreadPool& pool, const CastBlock& cast, SentBytes& sent);
 
 } // namespace banyan
 

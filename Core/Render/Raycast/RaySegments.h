@@ -2,8 +2,6 @@
 #ifndef banyan_Render_Raycast_RaySegments_h
 #define banyan_Render_Raycast_RaySegments_h
 
-#include "Base/RecycledMemory.h"
-
 #include <glm/vec2.hpp>
 
 #include <cstddef>
@@ -25,8 +23,7 @@ struct RaySegment
   std::uint32_t Pixel = 0;    ///< of the tile, x fastest
 };
 
-/// Many, again and again: from the system it would come cleared, which takes longer than drawing.
-using RaySegments = std::vector<RaySegment, RecycledMemory<RaySegment, LargeMemory::Smallest>>;
+using RaySegments = std::vector<RaySegment>;
 
 /// What a volume has along the rays of a tile of TileSamplings, or of a part of the tile. Segments
 /// of a pixel are in the order of the ray, and have no point in common.

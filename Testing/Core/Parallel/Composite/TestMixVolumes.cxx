@@ -262,7 +262,7 @@ TEST(MixVolumes, RanksThatDivideThePicture)
   EXPECT_LE(MaxDifference(mixed, alone), 1e-5);
 }
 
-TEST(MixVolumes, BandsAreOnePicture)
+TEST(MixVolumes, BlocksAreOnePicture)
 {
   const Field field;
   const RayScene scene = SceneOf();
@@ -273,20 +273,20 @@ TEST(MixVolumes, BandsAreOnePicture)
     {
       ThreadPool pool(1);
       SentBytes sent;
-      int bands = 0;
-      const auto cast = [&](std::size_t, const PixelRect& band, SegmentPicture& segments)
+      int blocks = 0;
+      const auto cast = [&](std::size_t, const PixelRect& block, SegmentPicture& segments)
       {
-        ++bands;
-        RayScene ofBand = scene;
-        ofBand.Viewport = band;
-        for (TileSegments& tile : field.Segments(ranks, ofBand))
+        ++blocks;
+        RayScene ofBlock = scene;
+        ofBlock.Viewport = block;
+        for (TileSegments& tile : field.Segments(ranks, ofBlock))
         {
           segments.Add(std::move(tile));
         }
         return 0.0f;
       };
-      const auto picture = MixInBands(ranks, 1, part, 2, pool, cast, sent);
-      EXPECT_GT(bands, 1);
+      const auto picture = MixInBlocks(ranks, 1, part, 2, pool, cast, sent);
+      EXPECT_GT(blocks, 1);
       ASSERT_EQ(picture != nullptr, ranks.Rank() == 2);
       for (int y = part.Lo.y; picture && y < part.Hi.y; ++y)
       {
