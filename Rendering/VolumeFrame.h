@@ -89,7 +89,7 @@ public:
   /// @param volumes in the picture
   float CastSegmentsOnWall(vtkRenderer* renderer, const OnWall& wall, const DepthPicture& depths,
     int volumes, const PixelRect& part, SegmentPicture& segments);
-  /// Tells what all parts of a picture took, with volumes that share the space.
+  /// What a picture took that was mixed.
   struct Mixing
   {
     int Volumes = 1;         ///< of the picture
@@ -97,6 +97,7 @@ public:
     SentBytes Sent;          ///< by this rank, for this volume
     std::size_t Picture = 0; ///< OnWall::Number
   };
+  /// Tells what all parts of a picture took, of volumes that share space.
   void SegmentsTook(vtkRenderer* renderer, const Mixing& mixing, bool onWall);
 
   /// Whether somebody goes on in front of the window while the picture is drawn, or moves the

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace banyan
 {
@@ -46,22 +47,39 @@ unsigned char KindOf(vtkProp* prop)
                                                                   : 0;
 }
 
-/// Whether a prop may show at pixels of a volume, and is not behind it.
-bool IsNotBehind(vtkProp* prop, const VolumeOnScreen& volume, const RayCamera& camera)
+/// A box in the world around some props; empty at first.
+struct PropBox
+{
+  glm::dvec3 Low{ std::numeric_limits<double>::infinity() };
+  glm::dvec3 High{ -std::numeric_limits<double>::infinity() };
+
+  bool Empty() const { return this->Low.x > this->High.x; }
+  void Add(const PropBox& other)
+  {
+    this->Low = glm::min(this->Low, other.Low);
+    this->High = glm::max(this->High, other.High);
+  }
+};
+
+PropBox BoxOf(vtkProp* prop)
 {
   const double* const bounds = prop->GetBounds();
   if (bounds == nullptr || !vtkMath::AreBoundsInitialized(bounds))
   {
-    return false;
+    return {};
   }
-  const glm::dvec3 low(bounds[0], bounds[2], bounds[4]);
-  const glm::dvec3 high(bounds[1], bounds[3], bounds[5]);
-  if (Intersection(camera.Footprint(low, high), volume.Viewport).Empty())
+  return { { bounds[0], bounds[2], bounds[4] }, { bounds[1], bounds[3], bounds[5] } };
+}
+
+/// Whether something in a box may show at pixels of a volume, and is not behind it.
+bool IsNotBehind(const PropBox& box, const VolumeOnScreen& volume, const RayCamera& camera)
+{
+  if (box.Empty() || Intersection(camera.Footprint(box.Low, box.High), volume.Viewport).Empty())
   {
     return false;
   }
   const DepthRelation relation =
-    RelationInDepth(volume.Body, { PlaceBox(low, high, glm::dmat4(1.0)) }, camera);
+    RelationInDepth(volume.Body, { PlaceBox(box.Low, box.High, glm::dmat4(1.0)) }, camera);
   return relation == DepthRelation::SecondNearer || relation == DepthRelation::Unknown;
 }
 
@@ -74,6 +92,20 @@ std::vector<unsigned char> UnitedOverRanks(
   for (std::size_t i = 0; i < all.size(); ++i)
   {
     united[i % mine.size()] |= all[i];
+  }
+  return united;
+}
+
+/// The box around what all ranks have: pieces of a surface may lie on any of them, and the picture
+/// must not depend on how they are dealt.
+PropBox UnitedOverRanks(Communicator& communicator, const PropBox& mine)
+{
+  std::vector<PropBox> all(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&mine, sizeof(mine), all.data());
+  PropBox united;
+  for (const PropBox& box : all)
+  {
+    united.Add(box);
   }
   return united;
 }
@@ -148,17 +180,30 @@ std::vector<unsigned char> FindNotInDepth(Communicator& communicator, vtkRendere
       bits[static_cast<std::size_t>(pair[1])] |= NotInDepth::SharedSpace;
     }
   }
+  const auto add = [&](unsigned char kind, const PropBox& box)
+  {
+    for (std::size_t i = 0; i < volumes.size(); ++i)
+    {
+      bits[i] |= IsNotBehind(box, volumes[i], camera) ? kind : 0;
+    }
+  };
+  PropBox surfaces;
   vtkPropCollection* const props = renderer->GetViewProps();
   vtkCollectionSimpleIterator at;
   props->InitTraversal(at);
   while (vtkProp* const prop = props->GetNextProp(at))
   {
     const unsigned char kind = KindOf(prop);
-    for (std::size_t i = 0; kind != 0 && i < volumes.size(); ++i)
+    if (kind == NotInDepth::Surface)
     {
-      bits[i] |= IsNotBehind(prop, volumes[i], camera) ? kind : 0;
+      surfaces.Add(BoxOf(prop));
+    }
+    else if (kind != 0)
+    {
+      add(kind, BoxOf(prop));
     }
   }
+  add(NotInDepth::Surface, UnitedOverRanks(communicator, surfaces));
   return UnitedOverRanks(communicator, bits);
 }
 

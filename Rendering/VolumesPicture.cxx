@@ -174,7 +174,7 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
   backdrop.SetCorner(this->View.Shown.Lo);
   this->TakeSurfaces(first, rect);
   backdrop.Read(*state.Communicator, this->Renderer, props, rect, state.RankOrderBehind, geometry);
-  this->Surfaces.Place(this->View, rect, backdrop);
+  Collective(*state.Communicator, [&] { this->Surfaces.Place(this->View, rect, backdrop); });
   const std::vector<PixelRect> parts = this->PartsOf(rect);
   const bool isWhole = parts.size() == 1 && this->View.ShowsAll();
   std::set<VolumeFrame*> failed;
@@ -250,11 +250,16 @@ void VolumesPicture::FindGroups(vtkBanyanVolumeMapper* first,
   WarnNotInDepth(first, frames, bits);
 }
 
-/// Takes translucent surfaces off the screen, if they are mixed.
+/// Collective: takes translucent surfaces off the screen, if they are mixed.
 void VolumesPicture::TakeSurfaces(vtkBanyanVolumeMapper* first, const PixelRect& rect)
 {
-  const bool all = !this->MixesSurfaces ||
-                   this->Surfaces.Take(this->Renderer, this->View, rect, this->CalledVolume);
+  if (!this->MixesSurfaces)
+  {
+    return;
+  }
+  bool all = true;
+  Collective(*first->State->Communicator,
+    [&] { all = this->Surfaces.Take(this->Renderer, this->View, rect, this->CalledVolume); });
   const unsigned char bits = all ? 0 : NotInDepth::Layers;
   const std::string note = TellNotInDepth(NotToldYet(bits, first->State->ToldNotInDepth));
   if (!note.empty())

@@ -121,8 +121,9 @@ class vtkRenderWindow;
  *
  * With several volumes in one renderer, on the same ranks, the first that is rendered draws all, in
  * the order of depth, wherever a plane separates their boxes. Others are mixed along each ray
- * (MixVolumes). For projections among these, and for translucent surfaces or other volumes that are
- * not behind them, a warning says once what is not exact.
+ * (MixVolumes), and with translucent surfaces that are not behind all of them. For projections
+ * among these, and for texts in space or other volumes that are not behind them, a warning says
+ * once what is not exact.
  *
  * Blend modes composite, maximum, minimum and average intensity; clipping planes, and cropping to
  * the inside of a box; shading; linear interpolation or, as vtkVolumeProperty has it by default,

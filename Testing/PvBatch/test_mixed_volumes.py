@@ -111,7 +111,7 @@ def options(stage, keep):
     for volume in stage.volumes:
         volume.display.InteractiveFrameSeconds = 0.0
     view.SMProxy.InteractiveRender()
-    if not SERVED:  # such frames come in fewer bits
+    if not SERVED:  # ParaView sends a client such frames in 5 bits per channel
         keep.take("moving", window_of(view))
     session.require((shown(view) == first).all(), "still again")
     return first

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Composite/MixVolumes.h"
 
-#include "Base/StopFlag.h"
 #include "Base/ThreadPool.h"
 #include "Base/Varint.h"
 #include "Parallel/Communicate/Collective.h"
@@ -122,10 +121,6 @@ void MixTiles(const MixedVolumes& space, ThreadPool& pool, TilePicture& picture)
   std::vector<std::unique_ptr<Worker>> workers(static_cast<std::size_t>(pool.Width()));
   const std::function<void(std::int64_t, int)> mix = [&](std::int64_t number, int worker)
   {
-    if (space.Stop)
-    {
-      space.Stop->Check();
-    }
     std::unique_ptr<Worker>& mine = workers[static_cast<std::size_t>(worker)];
     mine = mine ? std::move(mine) : std::make_unique<Worker>(space.Segments.size());
     const auto& [position, ofTile] = tiles[static_cast<std::size_t>(number)];

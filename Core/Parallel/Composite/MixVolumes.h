@@ -13,7 +13,6 @@
 namespace banyan
 {
 
-class StopFlag;
 class ThreadPool;
 
 /// Volumes that share space, as ranks have them along rays.
@@ -23,7 +22,6 @@ struct MixedVolumes
   std::vector<std::vector<TileSegments>> Segments;
   PixelRect Viewport;
   float TransmittanceLimit = 0.0f; ///< rays end when their transmittance is not above this
-  const StopFlag* Stop = nullptr;
 };
 
 /// Collective: the picture of volumes that share space. Tiles belong to ranks in turn. Each gets

@@ -327,12 +327,12 @@ void FieldFrames::Plan(Communicator& communicator, DistributedField& field, RayS
 void FieldFrames::PlanPart(Communicator& communicator, DistributedField& field, RayScene& whole,
   RayScene& scene, const Wish& wish, const ToleranceControl::Aim& aim, DrawnPicture& picture)
 {
-  const bool isOpen = scene.Depth.empty() || wish.Segments;
-  RayScene& planned = isOpen ? whole : scene;
+  const bool ofWhole = scene.Depth.empty() || wish.Segments;
+  RayScene& planned = ofWhole ? whole : scene;
   // All ranks go by the name that the first one has.
   Hash128 view = SceneOf(planned, wish);
   communicator.Broadcast(0, &view, sizeof(view));
-  if (!isOpen)
+  if (!ofWhole)
   {
     this->Plan(communicator, field, scene, view, wish, aim, picture);
     return;
