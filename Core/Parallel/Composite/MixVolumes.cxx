@@ -22,7 +22,7 @@ namespace
 {
 
 /// That segments of a block may take on a rank.
-constexpr double BlockBytes = 16e6;
+constexpr double BlockBytes = 48e6;
 /// Of segments, in what was not drawn yet.
 constexpr double LeastPerPixel = 512.0;
 /// Of the first block, of which nothing is known.

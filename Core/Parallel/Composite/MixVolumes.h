@@ -40,7 +40,7 @@ FloatImage MixVolumes(Communicator& communicator, MixedVolumes space, ThreadPool
 using CastBlock =
   std::function<float(std::size_t volume, const PixelRect& block, SegmentPicture& segments)>;
 
-/// Collective: the same of a picture, block after block, since segments take much memory: about 16
+/// Collective: the same of a picture, block after block, since segments take much memory: about 48
 /// MB on a rank. A block is rows of tiles, a part of one, or a tile where that alone has more.
 /// @param volumes how many there are
 /// @param sent this rank's bytes are added
